@@ -181,7 +181,10 @@ class ProvenParts {
       parallelBlocks(&progress, count, 1, [&](std::size_t i, std::size_t, std::size_t) {
         made[i] = make(first + static_cast<std::uint32_t>(i));
       });
-      for (std::uint32_t i = 0; i < count; ++i) sink.part(std::move(made[i]));
+      for (std::uint32_t i = 0; i < count; ++i) {
+        MeshPart part = std::exchange(made[i], {});  // freed behind this, whatever the sink does
+        sink.part(std::move(part));
+      }
     }
   }
 
@@ -296,7 +299,10 @@ void extractPart(ProcessTeam& team, PartSink& sink, const TetMapView& map,
     parts::runParts(&team, sink.neededGhostLayers(), map, options, all, context, statistics,
                     [&](parts::ProvenParts& maker, const PartsInfo& info) {
                       checked.begin(info);
-                      checked.part(maker.make(team.rank()));
+                      {
+                        Stage stage(context, "parts");
+                        checked.part(maker.make(team.rank()));
+                      }
                       checked.end();
                     });
     if (summary != nullptr) *summary = checked.result();

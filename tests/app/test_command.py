@@ -1440,7 +1440,7 @@ class Convert(CommandTest):
                 (["check", "a.mesh"], "Tets without a map: `hexhex mesh` makes hexahedra of them, or"),
                 (["info", "mfem.mesh"], "other files of MFEM, such as NURBS and nonconforming meshes, are not read"),
                 (["info", "a.obj"], ".obj files hold surfaces: `hexhex mesh` fills them"),
-                (["info", "a.bdf"], "meshio converts .bdf files: `pip install meshio[all]`"),
+                (["info", "a.bdf"], "meshio converts .bdf files from and to .vtu: `pip install meshio[all]`"),
                 (["extract", "a.fra", "-o", "b.vtu"], ".fra files hold frame fields, not maps: `hexhex map`")):
             self.assertIn(sentence, self.run_command(*arguments, expect=FILE_PROBLEM).stderr)
 

@@ -419,7 +419,43 @@ TEST(ForeignFiles, AbaqusInstancesOfSeveralParts) {
   EXPECT_EQ(abaqus(many).cells.size(), 2005U);
   many = "*Part, name=P\n" + std::string(100000, '*') + "\n*Node\n1, 0., 0., 0.\n*End Part\n";
   for (int i = 0; i < 200; ++i) many += concat("*Instance, name=x", i, ", part=P\n*End Instance\n");
-  expectFailureOf(abaqus, many, ErrorCode::TooLarge, "128 times the file");
+  expectFailureOf(abaqus, many, ErrorCode::TooLarge, "128 times the size");
+}
+
+TEST(ForeignFiles, PartsOfAbaqusWithoutInstancesAreReadWhereTheyStand) {
+  const std::string part = "*Part, name=P\n" + kInpNodes + kInpCells + "*End Part\n";
+  const HexMesh mesh = abaqus(part + "*Surface, name=top\nleft, S2\n");
+  EXPECT_EQ(mesh.cells.size(), 2U);
+  EXPECT_GT(mesh.features.quads.size(), abaqus(part).features.quads.size());
+  const std::string assembly = "*Assembly\n*Instance, name=P-1, part=P\n*End Instance\n";
+  EXPECT_EQ(abaqus(part + assembly).cells.size(), 2U);
+  const auto fails = [&](const std::string& file, const std::string& sentence) {
+    expectFailureOf(abaqus, file, ErrorCode::FileSyntax, sentence);
+  };
+  fails(replaced(part, "*End Part", "*Instance, name=P-1, part=P\n*End Instance\n*End Part") +
+            assembly,
+        "\"*instance\" cannot be in a part");
+  fails(part + "*Instance, name=P-1, part=P\n", "*END INSTANCE is missing");
+  fails(
+      part + assembly + "*Elset, elset=far, instance=P-1, generate\n1099511627776, 1099511627776\n",
+      "must be below 1099511627776");
+}
+
+/// As Abaqus/CAE and preprocessors lay them out: a file per part.
+TEST(ForeignFiles, InstancesOfAbaqusReadIncludedFilesOnce) {
+  const TemporaryFolder folder;
+  writeText(folder / "part.inc", kInpNodes + kInpCells);
+  std::string file = "*Part, name=P\n*Include, input=part.inc\n*End Part\n*Assembly\n";
+  for (int i = 0; i < 1100; ++i) {
+    file += concat("*Instance, name=P-", i, ", part=P\n*End Instance\n");
+  }
+  writeText(folder / "a.inp", file + "*End Assembly\n");
+  EXPECT_EQ(readHexMesh(folder / "a.inp").cells.size(), 2200U);
+  writeText(folder / "part.inc", "*Include, input=part.inc\n");
+  EXPECT_NE(failureOf([&] {
+              static_cast<void>(readHexMesh(folder / "a.inp"));
+            }).sentence.find("without end"),
+            std::string::npos);
 }
 
 /// Parts and assemblies both call their first set "Set-1" where nobody names it.

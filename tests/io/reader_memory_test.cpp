@@ -677,6 +677,9 @@ void addAbaqusBombs(std::vector<Bomb>& bombs) {
                             instances(kCopies);
                    }});
   bombs.push_back({"instances.inp", [=](std::size_t n) { return cube + instances(n / 150); }});
+  bombs.push_back({"dots.inp", [=](std::size_t n) {
+                     return cube + instances(1) + "*Elset, elset=a\n" + repeated(".", n) + "\n";
+                   }});
   bombs.push_back({"parts.inp", [=](std::size_t n) {
                      return repeated("*Part\n", n / 2) + cube + instances(n / 300);
                    }});

@@ -260,7 +260,9 @@ TEST(Parts, EndWhereASinkFails) {
       EXPECT_EQ(error.code(), ErrorCode::FileWrite);
     }
     EXPECT_FALSE(sink.ended);
-    EXPECT_LT(sink.received.size(), 500U);  // 3, and what the other thread did meanwhile
+    if (!anyOrder) {
+      EXPECT_EQ(sink.received.size(), 3U);
+    }
   }
 }
 

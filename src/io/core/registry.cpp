@@ -314,8 +314,7 @@ std::string adviceOn(const std::string& extension, FileContent content) {
   }
   if (std::find(kReadByMeshio.begin(), kReadByMeshio.end(), extension) != kReadByMeshio.end()) {
     return " meshio converts " + extension +
-           " files: `pip install meshio[all]`, then `meshio convert NAME" + std::string(extension) +
-           " NAME.vtu`.";
+           " files from and to .vtu: `pip install meshio[all]`, then `meshio convert FROM TO`.";
   }
   if (extension == ".fra") {
     return " .fra files hold frame fields, not maps: `hexhex map` makes a map of the tets alone.";

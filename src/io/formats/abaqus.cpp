@@ -4,11 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -119,8 +119,10 @@ class AbaqusReader {
 
   ElementLists read() {
     Array<char> room;
-    readFile({input_.text(room, stage_, "*"), input_.name(), input_.path()});
-    for (std::size_t i = 0; instances_.empty() && i < parts_.size(); ++i) readPart(parts_[i]);
+    const File& file = add({input_.text(room, stage_, "*"), input_.name(), input_.path()});
+    main_ = &file;
+    readLines({&file, 0, file.text.size()});
+    if (!prefix_.empty()) input_.fail(ErrorCode::FileSyntax, "*END INSTANCE is missing.");
     if (wanted_ == ElementParts::All) finish();
     return std::move(lists_);
   }
@@ -149,13 +151,24 @@ class AbaqusReader {
   static constexpr std::uint64_t kItemsPerByte = 2;  // of text: at most 16 times its size
   static constexpr std::uint64_t kItemsPerSide = 2 * sizeof(ElementSide) / sizeof(std::uint64_t);
 
-  void readFile(File&& opened) {
-    const File& file = files_.emplace_back(std::move(opened));
+  const File& add(File&& file) {
     textSize_ += file.text.size();
-    readLines({&file, 0, file.text.size()});
+    return files_.emplace(keyOf(file.path), std::move(file)).first->second;
+  }
+  [[nodiscard]] static std::filesystem::path keyOf(const std::filesystem::path& file) {
+    std::error_code unknown;
+    std::filesystem::path key = std::filesystem::canonical(file, unknown);
+    return unknown ? file : key;
   }
 
-  void readLines(const Part& lines) {
+  void readLines(Part lines) {
+    constexpr std::uint64_t kMostTimes = 128;
+    read_ += lines.end - lines.begin;
+    if (read_ > kMostTimes * textSize_) {
+      fail(concat("instances and *INCLUDE repeat lines to more than ", kMostTimes,
+                  " times the size of the files"),
+           ErrorCode::TooLarge);
+    }
     itemsLeft_ += kItemsPerByte * (lines.end - lines.begin);
     TextScanner scanner(lines.file->text.substr(0, lines.end), lines.file->name);
     scanner.moveTo(lines.begin);
@@ -168,7 +181,7 @@ class AbaqusReader {
       const AbaqusKeyword keyword = readKeyword();
       if (keyword.name == "*include") {
         include(keyword, lines.file->path);
-      } else if (keyword.name == "*part" && wanted_ == ElementParts::All) {
+      } else if (keyword.name == "*part" && wanted_ == ElementParts::All && hasInstances()) {
         skipPart(keyword.value("name"), *lines.file);
       } else {
         readBlock(keyword);
@@ -177,8 +190,32 @@ class AbaqusReader {
     scanner_ = outer;
   }
 
-  /// Instances read the part later.
+  /// Whether there are instances, which read parts; otherwise these are read where they stand.
+  bool hasInstances() {
+    if (!hasInstances_) {
+      const std::string_view line = line_;
+      hasInstances_ = hasInstances(*main_);
+      line_ = line;
+    }
+    return *hasInstances_;
+  }
+  bool hasInstances(const File& file) {
+    if (!searched_.insert(&file).second) return false;
+    TextScanner scanner(file.text, file.name);
+    TextScanner* const outer = std::exchange(scanner_, &scanner);
+    bool found = false;
+    while (!found && nextLine()) {
+      if (!line_.starts_with("*")) continue;
+      const AbaqusKeyword keyword = readKeyword();
+      found = keyword.name == "*instance" ||
+              (keyword.name == "*include" && hasInstances(included(keyword, file.path)));
+    }
+    scanner_ = outer;
+    return found;
+  }
+
   void skipPart(const std::string& name, const File& file) {
+    if (inPart_) fail("a part begins in another one");
     const std::size_t begin = scanner_->position();
     std::size_t end = begin;
     for (; nextLine(); end = scanner_->position()) {
@@ -192,16 +229,6 @@ class AbaqusReader {
     }
     partNumbers_.emplace(name, parts_.size());
     parts_.push_back({&file, begin, end});
-  }
-
-  void readPart(const Part& part) {
-    constexpr std::uint64_t kMostTimes = 128;
-    copied_ += part.end - part.begin;
-    if (copied_ > kMostTimes * textSize_) {
-      fail(concat("instances repeat parts to more than ", kMostTimes, " times the file"),
-           ErrorCode::TooLarge);
-    }
-    readLines(part);
   }
 
   /// Moves to the next line that is neither blank nor a comment. @return false at the end of the
@@ -248,6 +275,12 @@ class AbaqusReader {
            ErrorCode::FileUnsupported);
     }
     if (wanted_ == ElementParts::Types && keyword.name != "*element") return;
+    constexpr std::array<std::string_view, 4> kOutsideParts = {"*assembly", "*endassembly",
+                                                               "*instance", "*endinstance"};
+    if (inPart_ && std::find(kOutsideParts.begin(), kOutsideParts.end(), keyword.name) !=
+                       kOutsideParts.end()) {
+      fail(quoted(std::string_view(keyword.name)) + " cannot be in a part");
+    }
     if (keyword.name == "*node") {
       readNodes(keyword);
     } else if (keyword.name == "*element") {
@@ -256,7 +289,7 @@ class AbaqusReader {
       readSet(keyword, keyword.value("nset"), nodeSets_);
     } else if (keyword.name == "*elset") {
       readSet(keyword, keyword.value("elset"), elementSets_);
-      if (!keyword.has("internal")) listedSets_.push_back(keyOf(keyword.value("elset")));
+      if (!keyword.has("internal")) listedSets_.push_back(prefix_ + keyword.value("elset"));
     } else if (keyword.name == "*surface") {
       readSurface(keyword);
     } else if (keyword.name == "*heading") {
@@ -296,8 +329,11 @@ class AbaqusReader {
     if (!instances_.emplace(name, scope_).second) {
       fail("two instances have the name " + quoted(std::string_view(name)));
     }
+    longest_ = std::max(longest_, name.size());
     const auto part = partNumbers_.find(keyword.value("part"));
-    if (part == partNumbers_.end() && keyword.has("part")) fail("the instance is of no part above");
+    if (part == partNumbers_.end() && keyword.has("part")) {
+      fail("no part above has the name " + quoted(std::string_view(keyword.value("part"))));
+    }
     prefix_ = name + '.';
     firstPoint_ = lists_.points.size();
     for (const std::size_t count : {3U, 7U}) {
@@ -308,7 +344,10 @@ class AbaqusReader {
         place_.push_back(word.empty() ? 0 : real(word));
       }
     }
-    if (part != partNumbers_.end()) readPart(parts_[part->second]);
+    if (part == partNumbers_.end()) return;
+    inPart_ = true;
+    readLines(parts_[part->second]);
+    inPart_ = false;
   }
 
   void placeInstance() {
@@ -334,13 +373,23 @@ class AbaqusReader {
   }
 
   void include(const AbaqusKeyword& keyword, const std::filesystem::path& path) {
+    constexpr int kDeepest = 32;
+    if (depth_ == kDeepest) fail("files include each other without end");
+    const File& file = included(keyword, path);
+    ++depth_;
+    readLines({&file, 0, file.text.size()});
+    --depth_;
+  }
+
+  const File& included(const AbaqusKeyword& keyword, const std::filesystem::path& path) {
     const std::string name = keyword.value("input");
     if (name.empty()) fail("*INCLUDE needs the name of a file: INPUT=...");
     if (path.empty()) fail("a text in memory cannot include files", ErrorCode::FileUnsupported);
-    constexpr int kDeepest = 32;
-    constexpr int kMost = 1000;
-    if (depth_ == kDeepest || ++includes_ > kMost) fail("files include each other without end");
     const std::filesystem::path file = path.parent_path() / name;
+    const auto known = files_.find(keyOf(file));
+    if (known != files_.end()) return known->second;
+    constexpr std::size_t kMost = 1000;
+    if (files_.size() > kMost) fail(concat("more than ", kMost, " files are included"));
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(file, unknown)) {
       fail("there is no file " + quoted(std::string_view(file.string())) + " to include",
@@ -348,9 +397,7 @@ class AbaqusReader {
     }
     Array<char> bytes = readWholeFile(file, stage_);
     const std::string_view text = withoutByteOrderMark(asText(bytes));
-    ++depth_;
-    readFile({text, file.string(), file, std::move(bytes)});
-    --depth_;
+    return add({text, file.string(), file, std::move(bytes)});
   }
 
   void readNodes(const AbaqusKeyword& keyword) {
@@ -358,7 +405,7 @@ class AbaqusReader {
       fail("nodes in cylindrical or spherical coordinates are not supported",
            ErrorCode::FileUnsupported);
     }
-    const std::string set = keyOf(keyword.value("nset"));
+    const std::string set = keyOf(keyword.value("nset"), 'n');
     std::vector<std::uint64_t>* const items = set.empty() ? nullptr : &nodeSets_[set];
     ofNodeSets_ |= scope_;
     while (nextData()) {
@@ -382,7 +429,7 @@ class AbaqusReader {
     ElementBlock& block = lists_.blocks.emplace_back();
     block.type = type.cells;
     block.nodesEach = type.nodes;
-    const std::string set = keyOf(keyword.value("elset"));
+    const std::string set = keyOf(keyword.value("elset"), 'e');
     if (!set.empty()) blockSets_.push_back(set);
     if (scope_ == kOfAssembly && type.nodes > 0) {
       fail("the assembly has elements of its own, which are not read. Give them a part",
@@ -445,7 +492,7 @@ class AbaqusReader {
 
   void readSet(const AbaqusKeyword& keyword, const std::string& name, Sets& sets) {
     if (name.empty()) fail("the set has no name");
-    const std::string key = keyOf(name);
+    const std::string key = keyOf(name, &sets == &nodeSets_ ? 'n' : 'e');
     std::vector<std::uint64_t>& set = sets[key];
     const std::uint64_t ofAssembly = &sets == &nodeSets_ ? ofNodeSets_ : ofElementSets_;
     Scope scope = {prefix_, instances_.size() > 1 ? scope_ : scope_ & ofAssembly};
@@ -462,12 +509,12 @@ class AbaqusReader {
         if (word.empty()) continue;
         std::uint64_t number = 0;
         if (parseInteger(word, number)) {
-          set.push_back(scope.numbers | number);
+          set.push_back(scoped(word, kOfMember, scope.numbers));
           continue;
         }
         const Named named = nameOf(word, scope, sets);
         if (parseInteger(named.word, number)) {
-          set.push_back(named.scope | number);
+          set.push_back(scoped(named.word, kOfMember, named.scope));
           continue;
         }
         const auto other = sets.find(named.key);
@@ -516,7 +563,7 @@ class AbaqusReader {
   [[nodiscard]] Named nameOf(std::string_view word, Scope scope, const Sets& sets) const {
     const bool quotes = word.size() > 1 && word.front() == '"' && word.back() == '"';
     std::string name = lowerCase(quotes ? word.substr(1, word.size() - 2) : word);
-    for (std::size_t dot = name.find('.'); dot < name.size(); dot = name.find('.', dot + 1)) {
+    for (std::size_t dot = name.find('.'); dot <= longest_; dot = name.find('.', dot + 1)) {
       const auto found = instances_.find(name.substr(0, dot));
       if (found == instances_.end() || sets.contains(scope.prefix + name)) continue;
       scope = {found->first + '.', found->second};
@@ -529,23 +576,24 @@ class AbaqusReader {
     return {name, scope.numbers, key};
   }
   /// The name of a set or surface, if it has one, with the instance in front.
-  std::string keyOf(const std::string& name) {
+  /// @param kind  of nodes, elements or surfaces, which may have the same name
+  std::string keyOf(const std::string& name, char kind) {
     if (name.empty()) return {};
     std::string key = prefix_ + name;
-    if (plainNames_.emplace(key, name).second) ++uses_[name];
+    if (plainNames_.emplace(kind + key, name).second) ++uses_[kind + name];
     return key;
   }
 
   /// Adds a range "first, last, step" to a set.
   void addRange(std::string_view rest, std::uint64_t offset, std::vector<std::uint64_t>& set) {
-    const std::uint64_t first = integer(takeField(rest), "the first of a range");
-    const std::uint64_t last = integer(takeField(rest), "the last of a range");
+    const std::uint64_t first = scoped(takeField(rest), "the first of a range", offset);
+    const std::uint64_t last = scoped(takeField(rest), "the last of a range", offset);
     const std::string_view word = takeField(rest);
     const std::uint64_t step = word.empty() ? 1 : integer(word, "the step of a range");
     if (step == 0 || last < first) fail("a range is \"first, last, step\", upwards");
     takeRoom((last - first) / step + 1);
     for (std::uint64_t i = first;; i += step) {
-      set.push_back(offset | i);
+      set.push_back(i);
       if (last - i < step) break;
     }
   }
@@ -560,7 +608,7 @@ class AbaqusReader {
 
   void readSurface(const AbaqusKeyword& keyword) {
     const std::string type = keyword.value("type");
-    Surface& surface = surfaces_.emplace_back(Surface{keyOf(keyword.value("name")), {}});
+    Surface& surface = surfaces_.emplace_back(Surface{keyOf(keyword.value("name"), 's'), {}});
     const Scope scope = {prefix_, instances_.size() > 1 ? scope_ : 0};
     while (nextData()) {
       if (!type.empty() && type != "element") continue;
@@ -572,8 +620,8 @@ class AbaqusReader {
       const auto side = static_cast<std::uint8_t>(face[1] - '0');
       const auto set = elementSets_.find(elements.key);
       if (set == elementSets_.end()) {
-        const std::uint64_t number = integer(elements.word, "an element or a set of them");
-        surface.sides.push_back({elements.scope | number, side, 0});
+        surface.sides.push_back(
+            {scoped(elements.word, "an element or a set of them", elements.scope), side, 0});
       } else {
         takeRoom(kItemsPerSide * set->second.size());
         for (const std::uint64_t element : set->second) {
@@ -588,14 +636,15 @@ class AbaqusReader {
     if (nodeNumbers_.empty()) {
       input_.fail(ErrorCode::FileUnsupported, "the file has no *NODE section.");
     }
-    const NodeTags nodes = nodesByNumber(nodeNumbers_, input_, kOfInstance - 1);
-    lists_.nameNodes(nodes, input_, "*NODE section", kOfInstance - 1);
+    const std::uint64_t digits = instances_.empty() ? kAllDigits : kOfInstance - 1;
+    const NodeTags nodes = nodesByNumber(nodeNumbers_, input_, digits);
+    lists_.nameNodes(nodes, input_, "*NODE section", digits);
     tagRegions();
     tagSurfaces();
     for (const std::size_t corners : {4U, 3U, 2U}) tagFacets(corners, nodes);
     for (auto& [name, set] : nodeSets_) {
       NodeSet& added = lists_.nodeSets.emplace_back(
-          NodeSet{ownName(name), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
+          NodeSet{ownName(name, 'n'), static_cast<std::int32_t>(lists_.nodeSets.size()) + 1, {}});
       for (const std::uint64_t number : set) {
         const Index node = nodes.find(number);
         if (node != kNone) added.nodes.push_back(node);
@@ -604,15 +653,16 @@ class AbaqusReader {
     }
   }
 
-  /// The name of a set or surface without its instance, unless another would have the same.
-  [[nodiscard]] const std::string& plainName(const std::string& key) const {
-    const auto plain = plainNames_.find(key);
-    return plain != plainNames_.end() && uses_.at(plain->second) == 1 ? plain->second : key;
+  /// The name of a set or surface without its instance, unless another of its kind would have the
+  /// same.
+  [[nodiscard]] const std::string& plainName(const std::string& key, char kind) const {
+    const auto plain = plainNames_.find(kind + key);
+    return plain != plainNames_.end() && uses_.at(kind + plain->second) == 1 ? plain->second : key;
   }
 
   /// The plain name of a group without the prefix "E_", "N_" or "S_" that the writer adds.
-  [[nodiscard]] std::string ownName(const std::string& key) const {
-    const std::string& name = plainName(key);
+  [[nodiscard]] std::string ownName(const std::string& key, char kind) const {
+    const std::string& name = plainName(key, kind);
     const bool prefixed = name.size() > 2 && name[1] == '_' &&
                           std::string_view("ens").find(name[0]) != std::string_view::npos;
     return prefixed && (isOwn_ || tagInGroupName(name.substr(2))) ? name.substr(2) : name;
@@ -646,18 +696,18 @@ class AbaqusReader {
     const std::vector<std::string> later = sections_.empty() ? volumeSets() : sections_;
     names.insert(names.end(), later.begin(), later.end());
     for (const auto& [name, set] : elementSets_) {
-      if (ownName(name) != plainName(name)) names.push_back(name);
+      if (ownName(name, 'e') != plainName(name, 'e')) names.push_back(name);
     }
     GroupTags tags;
-    for (const std::string& name : names) tags.reserve(ownName(name));
+    for (const std::string& name : names) tags.reserve(ownName(name, 'e'));
     std::set<std::string> done;
     ElementTags regions;
     for (const std::string& name : names) {
       const auto set = elementSets_.find(name);
       if (set == elementSets_.end()) continue;
       if (!done.insert(name).second) continue;
-      const std::int32_t tag = tags.next(ownName(name));
-      lists_.addName(3, tag, ownName(name));
+      const std::int32_t tag = tags.next(ownName(name, 'e'));
+      lists_.addName(3, tag, ownName(name, 'e'));
       for (const std::uint64_t element : set->second) regions.add(element, tag);
     }
     regions.sort();
@@ -666,10 +716,10 @@ class AbaqusReader {
 
   void tagSurfaces() {
     lists_.sideNumbers = kAbaqusSides;
-    for (const Surface& surface : surfaces_) facetTags_.reserve(ownName(surface.name));
+    for (const Surface& surface : surfaces_) facetTags_.reserve(ownName(surface.name, 's'));
     for (Surface& surface : surfaces_) {
-      const std::int32_t tag = facetTags_.next(ownName(surface.name));
-      lists_.addName(2, tag, ownName(surface.name));
+      const std::int32_t tag = facetTags_.next(ownName(surface.name, 's'));
+      lists_.addName(2, tag, ownName(surface.name, 's'));
       for (ElementSide side : surface.sides) {
         side.tag = tag;
         lists_.sides.push_back(side);
@@ -692,8 +742,8 @@ class AbaqusReader {
             std::none_of(set.begin(), set.end(), isUntagged)) {
           continue;
         }
-        const std::int32_t tag = facetTags_.next(plainName(name));
-        lists_.addName(corners == 2 ? 1 : 2, tag, plainName(name));
+        const std::int32_t tag = facetTags_.next(plainName(name, 'e'));
+        lists_.addName(corners == 2 ? 1 : 2, tag, plainName(name, 'e'));
         for (const std::uint64_t number : set) {
           if (isUntagged(number)) facets[number].second = tag;
         }
@@ -707,10 +757,16 @@ class AbaqusReader {
     if (parseInteger(word, number)) return number;
     fail(concat("expected ", what, ", found ", quoted(word)));
   }
-  [[nodiscard]] std::uint64_t scoped(std::string_view word, const char* what) const {
+  static constexpr const char* kOfMember = "a member of a set";
+  /// A number of the file with what such numbers begin with.
+  [[nodiscard]] std::uint64_t scoped(std::string_view word, const char* what,
+                                     std::uint64_t scope) const {
     const std::uint64_t number = integer(word, what);
-    if (number < kOfInstance || instances_.empty()) return scope_ | number;
-    fail(concat(number, " is no number for ", what));
+    if (number < kOfInstance || instances_.empty()) return scope | number;
+    fail(concat("in an assembly, ", what, " must be below ", kOfInstance, ", found ", number));
+  }
+  [[nodiscard]] std::uint64_t scoped(std::string_view word, const char* what) const {
+    return scoped(word, what, scope_);
   }
   [[nodiscard]] double real(std::string_view word) const {
     double value = 0;
@@ -742,13 +798,17 @@ class AbaqusReader {
   bool begun_ = false;
   bool isOwn_ = false;  ///< whether this library wrote the file
   int depth_ = 0;       ///< nesting depth of *INCLUDE
-  int includes_ = 0;
   std::vector<Part> parts_;
   std::map<std::string, std::size_t> partNumbers_;
-  std::deque<File> files_;
+  bool inPart_ = false;
+  std::map<std::filesystem::path, File> files_;
+  const File* main_ = nullptr;
+  std::set<const File*> searched_;  ///< for instances
+  std::optional<bool> hasInstances_;
   std::uint64_t textSize_ = 0;                      ///< of all files
-  std::uint64_t copied_ = 0;                        ///< text of parts that instances have read
+  std::uint64_t read_ = 0;                          ///< of it, as often as it was
   std::map<std::string, std::uint64_t> instances_;  ///< and what their numbers begin with
+  std::size_t longest_ = 0;                         ///< of their names
   std::string prefix_;               ///< of names: the instance that is read, and a dot
   std::uint64_t scope_ = 0;          ///< what numbers begin with,
   std::uint64_t ofNodeSets_ = 0;     ///< in sets if the assembly has nodes

@@ -51,6 +51,9 @@ constexpr std::int64_t kCgnsMixed = 20;
 constexpr std::int64_t kCgnsPolygons = 22;
 constexpr std::int64_t kCgnsPolyhedra = 23;
 
+/// A face of a structured zone takes as much memory as so many members of a condition.
+constexpr std::uint64_t kMembersOfFace = 8;
+
 /// An element type of the standard.
 struct CgnsType {
   std::int64_t number;
@@ -359,7 +362,7 @@ class CgnsReader {
           ofCells ? std::nullopt : axisOf(condition, location, range);
       const ZoneGrid grid = ofVertices ? zone.grid : zone.grid.between(across);
       if (!grid.has(range.first) || !grid.has(range.last)) failCondition(condition);
-      takeMembers(2 * range.count());  // faces take more memory
+      takeMembers((across ? kMembersOfFace : 1) * range.count());
       if (!across) {
         range.forEach([&](const ZonePlace& place) {
           const std::uint64_t number = grid.numberOf(place) + 1 + (ofVertices ? 0 : zone.before);
@@ -511,11 +514,8 @@ class CgnsReader {
     for (const std::string& property : nodes(path, "GridConnectivityProperty_t")) {
       if (!nodes(property, "Periodic_t").empty()) return {};
     }
-    const std::string donor = withoutSpaces(nameOf(textOf(path)));
-    const auto other = std::find_if(zones_.begin(), zones_.end(), [&](const Zone& each) {
-      return withoutSpaces(nameOf(each.path)) == donor;
-    });
-    if (other == zones_.end()) failConnection(path);
+    Zone* const other = zoneNamed(textOf(path), zone);
+    if (other == nullptr) failConnection(path);
     const std::vector<ZoneRange> ranges = rangesIn(zone.axes, path, "Point");
     const std::vector<ZoneRange> donors = rangesIn(other->axes, path, "Point", "Donor");
     const std::vector<Index> here = verticesOf(zone, ranges, path);
@@ -527,7 +527,7 @@ class CgnsReader {
     std::vector<std::pair<Index, Index>> pairs(here.size());
     for (std::size_t i = 0; i < here.size(); ++i) pairs[i] = {here[i], there[i]};
     // Some programs name a connection on one side only.
-    if (&*other != &zone && !pairs.empty()) zone.isJoined = other->isJoined = true;
+    if (other != &zone && !pairs.empty()) zone.isJoined = other->isJoined = true;
     return pairs;
   }
   [[nodiscard]] std::vector<Index> verticesOf(const Zone& zone,
@@ -567,6 +567,21 @@ class CgnsReader {
   [[noreturn]] void failConnection(const std::string& path) const {
     input_.fail(ErrorCode::FileSyntax, "the connection \"", path,
                 "\" does not name vertices of two zones in pairs.");
+  }
+  /// The zone that a connection names, perhaps with the base in front; null if there is none.
+  [[nodiscard]] Zone* zoneNamed(const std::string& donor, const Zone& from) {
+    const std::string base = from.path.substr(0, from.path.rfind('/') + 1);
+    const auto find = [this](const auto& fits) {
+      const auto found = std::find_if(zones_.begin(), zones_.end(), fits);
+      return found == zones_.end() ? nullptr : &*found;
+    };
+    for (const std::string& path : {base + donor, donor}) {
+      if (Zone* const zone = find([&](const Zone& each) { return each.path == path; })) return zone;
+    }
+    return find([&](const Zone& each) {
+      return each.path.starts_with(base) &&
+             withoutSpaces(nameOf(each.path)) == withoutSpaces(nameOf(donor));
+    });
   }
   /// Gmsh names a zone with underscores where connections to it have spaces.
   [[nodiscard]] static std::string withoutSpaces(std::string name) {

@@ -64,6 +64,7 @@ std::optional<MfemSpace> mfemSpace(std::string_view name) {
     if (!name.starts_with(space.name)) continue;
     const std::string_view digit = name.substr(space.name.size());
     if (space.order > 0 && digit.empty()) return space;
+    if (space.order > 0) continue;
     space.order = digit.size() == 1 ? digit[0] - '0' : 0;
     if (space.order >= 1 && space.order <= kMaxOrder) return space;
   }
@@ -371,7 +372,10 @@ class MfemReader {
       for (std::size_t k = 0; k < each; ++k) {
         nodes[order[k]] = nodeAt(space.perCell ? each * c + order[k] : row[k]);
       }
-      if (moves) evaluate(rows, static_cast<std::size_t>(space.order) + 1, nodes);
+      if (moves) {
+        evaluate(rows, static_cast<std::size_t>(space.order) + 1, nodes);
+        requireFinite(nodes, c);
+      }
       for (std::size_t k = 0; k < each; ++k) {
         Vec3& point = lists_.points[row[k]];
         if (!known[row[k]]) point = nodes[order[k]];
@@ -385,6 +389,16 @@ class MfemReader {
     const std::size_t room = (scanner_.text().size() - scanner_.position()) / kFewestBytesOfNode;
     if (nodes <= room) return;
     scanner_.fail(ErrorCode::FileSyntax, lacksRoom(std::to_string(nodes), "nodes", room));
+  }
+
+  void requireFinite(const std::vector<Vec3>& nodes, std::size_t cell) const {
+    for (const Vec3& node : nodes) {
+      for (const double x : node) {
+        if (std::isfinite(x)) continue;
+        scanner_.fail(ErrorCode::NotFinite, Place{PlaceKind::Cell, cell}, "a node of cell ", cell,
+                      " is not finite between the places that the file gives.");
+      }
+    }
   }
 
   void requireHexahedraOnly() const {
