@@ -178,7 +178,7 @@ def write_cgns(file, kind):
         side = "FaceCenter" if kind == "cgns-faces" else "KFaceCenter"
         for zone, name, location, array, numbers in (
                 (first, "west", "Vertex", "Range", [[1, 1, 1], [1, 3, 2]]),
-                (second, "north", "IFaceCenter", "List", [[1, 1, 1], [1, 1, 2]]),
+                (second, "north", "IFaceCenter", "List", [[1, 1, 1], [1, 1, 2]] * (5000 if kind == "cgns-many" else 1)),
                 (second, "east", side, "Range", [[1, 1, 3], [2, 1, 3]]),
                 (first, "corner", "Vertex", "List", [[1, 3, 2]])):
             bc = node(zone.get("ZoneBC") or node(zone, "ZoneBC", "ZoneBC_t"), name, "BC_t", "C1", "BCWall")
@@ -196,7 +196,7 @@ def write_cgns(file, kind):
             node(node(base, family, "Family_t"), "inflow", "FamilyName_t", "C1", "inflow")
         else:
             node(base, family, "Family_t")
-        if kind[5:] in ("blocks", "lists", "once", "loop", "ring", "rind", "flat", "far", "faces"):
+        if kind[5:] in ("blocks", "lists", "once", "many", "loop", "ring", "rind", "flat", "far", "faces"):
             write_blocks(base)
         elif kind in ("cgns20", "cgns27"):
             # As the standard (SIDS) numbers the nodes: corners, edges at the bottom, upright and at the

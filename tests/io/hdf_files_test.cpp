@@ -210,6 +210,7 @@ TEST(HdfFiles, StructuredCgns) {
   EXPECT_NE(sentence("cgns-far").find("has 18 vertices, but its size is 3 x 65536 x 32768"),
             std::string::npos);
   EXPECT_NE(sentence("cgns-faces").find("across which axis"), std::string::npos);
+  EXPECT_NE(sentence("cgns-many").find("far more members"), std::string::npos);
   EXPECT_NE(sentence("cgns-flat").find("does not have three axes"), std::string::npos);
 }
 

@@ -372,11 +372,12 @@ class CgnsReader {
       }
       // Vertices of a plane: all but the last ones are the lowest corners of faces.
       if (ofVertices) range.last = ZoneGrid{range.last}.between(across).size;
+      const std::uint64_t first = lastFace_ + 1;
       range.forEach([&](const ZonePlace& corner) {
         const Quad v = zone.grid.faceAt(zone.firstPoint, *across, corner);
         flats_.push_back({++lastFace_, v.size(), v});
-        faces.ranges.emplace_back(lastFace_, lastFace_);
       });
+      if (lastFace_ >= first) faces.ranges.emplace_back(first, lastFace_);
     }
     if (ofVertices && !group.ranges.empty()) addNodes(zone, group);
     if (ofCells) volumeGroups_.push_back(std::move(group));
@@ -451,7 +452,8 @@ class CgnsReader {
   void takeMembers(std::uint64_t count) {
     if (count > 1) members_ += count;
     constexpr std::uint64_t kMostTimes = 8;
-    if (members_ <= kMostTimes * (lists_.points.size() + lastNumber_)) return;
+    constexpr std::uint64_t kFew = 1U << 16;  // small zones have more faces than vertices
+    if (members_ <= kMostTimes * (lists_.points.size() + lastNumber_) + kFew) return;
     input_.fail(ErrorCode::TooLarge,
                 "conditions and connections have far more members than the file has elements.");
   }
@@ -472,16 +474,7 @@ class CgnsReader {
   void connect() {
     if (zones_.size() == 1 && zones_[0].axes == 1) return;
     DisjointSets same(lists_.points.size());
-    for (Zone& zone : zones_) {
-      for (const std::string& all : nodes(zone.path, "ZoneGridConnectivity_t")) {
-        for (const bool byRange : {false, true}) {
-          const char* const label = byRange ? "GridConnectivity1to1_t" : "GridConnectivity_t";
-          for (const std::string& to : nodes(all, label)) {
-            for (const auto& [a, b] : sharedBy(zone, to, byRange)) same.unite(a, b);
-          }
-        }
-      }
-    }
+    for (Zone& zone : zones_) connect(zone, same);
     for (const Zone& zone : zones_) {
       if (zone.isJoined || zones_.size() == 1) continue;
       input_.fail(ErrorCode::FileUnsupported,
@@ -501,6 +494,17 @@ class CgnsReader {
     for (ElementBlock& block : lists_.blocks) renumber(block.nodes);
     for (NodeSet& set : lists_.nodeSets) renumber(set.nodes);
     for (Flat& flat : flats_) renumber(flat.nodes);
+  }
+
+  void connect(Zone& zone, DisjointSets& same) {
+    for (const std::string& all : nodes(zone.path, "ZoneGridConnectivity_t")) {
+      for (const bool byRange : {false, true}) {
+        const char* const label = byRange ? "GridConnectivity1to1_t" : "GridConnectivity_t";
+        for (const std::string& to : nodes(all, label)) {
+          for (const auto& [a, b] : sharedBy(zone, to, byRange)) same.unite(a, b);
+        }
+      }
+    }
   }
 
   /// Pairs of vertices identified by a connection; none for a periodic one.
