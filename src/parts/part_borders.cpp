@@ -17,9 +17,9 @@ namespace {
 struct SharedSide {
   lattice::UInt128 vertices;  ///< ascending
   std::uint64_t number;       ///< global, of its cell
+  Index cell;                 ///< own, or an index in the list of other cells
+  bool isOwn;
   std::uint8_t side;
-  Index cell;   ///< own, or kNone
-  Index other;  ///< index in the list of other cells, or kNone
 };
 
 struct Pairing {
@@ -46,7 +46,7 @@ constexpr std::array<lattice::CellCornerSet, 6> kSideCorners = [] {
 }();
 
 /// @param isShared  per vertex: 1 if it is
-void addSides(const Hex& corners, std::uint64_t number, Index cell, Index other,
+void addSides(const Hex& corners, std::uint64_t number, std::size_t cell, bool isOwn,
               const Array<std::uint8_t>& isShared, std::vector<SharedSide>& sides) {
   lattice::CellCornerSet shared = 0;
   for (std::size_t k = 0; k < 8; ++k) {
@@ -55,7 +55,8 @@ void addSides(const Hex& corners, std::uint64_t number, Index cell, Index other,
   if (shared == 0) return;
   for (std::uint8_t side = 0; side < 6; ++side) {
     if ((kSideCorners[side] & ~shared) != 0) continue;
-    sides.push_back({nameOf(adjacency::faceVertices(corners, side)), number, side, cell, other});
+    sides.push_back({nameOf(adjacency::faceVertices(corners, side)), number,
+                     static_cast<Index>(cell), isOwn, side});
   }
 }
 
@@ -81,8 +82,7 @@ class FacePairs {
 
  private:
   [[nodiscard]] Quad quadOf(const SharedSide& side) const {
-    const Hex& corners =
-        side.cell != kNone ? part_.mesh.cells[side.cell] : around_[side.other].corners;
+    const Hex& corners = side.isOwn ? part_.mesh.cells[side.cell] : around_[side.cell].corners;
     return adjacency::faceVertices(corners, side.side);
   }
   void pairUp(std::span<const SharedSide> run) {
@@ -96,10 +96,10 @@ class FacePairs {
     }
   }
   void add(const SharedSide& a, const SharedSide& b) {
-    if ((a.cell == kNone) == (b.cell == kNone)) return;
-    const SharedSide& own = a.cell != kNone ? a : b;
-    const SharedSide& other = a.cell != kNone ? b : a;
-    const std::uint32_t neighbour = around_[other.other].part;
+    if (a.isOwn == b.isOwn) return;
+    const SharedSide& own = a.isOwn ? a : b;
+    const SharedSide& other = a.isOwn ? b : a;
+    const std::uint32_t neighbour = around_[other.cell].part;
     const SharedSide& named = part_.part < neighbour ? own : other;
     pairs_.push_back({neighbour, named.number, named.side, {own.cell, own.side, other.number}});
   }
@@ -148,12 +148,15 @@ void findNeighbours(MeshPart& part, std::span<const BorderCell> around) {
   assert(std::ranges::is_sorted(around, {}, &BorderCell::number));
   const Array<std::uint8_t> isShared = shareVertices(part, around);
   std::vector<SharedSide> sides;
+  // Nearly all are between two cells; growing would touch twice as many pages.
+  constexpr std::size_t kSidesPerVertex = 3;
+  sides.reserve(kSidesPerVertex *
+                static_cast<std::size_t>(std::count(isShared.begin(), isShared.end(), 1)));
   for (std::size_t c = 0; c < part.ownCells; ++c) {
-    addSides(part.mesh.cells[c], part.globalCells[c], static_cast<Index>(c), kNone, isShared,
-             sides);
+    addSides(part.mesh.cells[c], part.globalCells[c], c, true, isShared, sides);
   }
   for (std::size_t i = 0; i < around.size(); ++i) {
-    addSides(around[i].corners, around[i].number, kNone, static_cast<Index>(i), isShared, sides);
+    addSides(around[i].corners, around[i].number, i, false, isShared, sides);
   }
   std::vector<Pairing> pairs = FacePairs(part, around).find(sides);
   std::sort(pairs.begin(), pairs.end(), [](const Pairing& a, const Pairing& b) {
