@@ -86,6 +86,12 @@ class FacePairs {
     return adjacency::faceVertices(corners, side.side);
   }
   void pairUp(std::span<const SharedSide> run) {
+    // Nearly all are alone or a pair.
+    if (run.size() == 1 || (run.size() == 2 && run[0].isOwn == run[1].isOwn)) return;
+    if (run.size() == 2) {
+      if (adjacency::areOpposite(quadOf(run[0]), quadOf(run[1]))) add(run[0], run[1]);
+      return;
+    }
     std::vector<bool> taken(run.size(), false);
     for (std::size_t i = 0; i < run.size(); ++i) {
       for (std::size_t j = i + 1; j < run.size() && !taken[i]; ++j) {
