@@ -86,17 +86,11 @@ class FacePairs {
     return adjacency::faceVertices(corners, side.side);
   }
   void pairUp(std::span<const SharedSide> run) {
-    // Nearly all are alone or a pair.
-    if (run.size() == 1 || (run.size() == 2 && run[0].isOwn == run[1].isOwn)) return;
-    if (run.size() == 2) {
-      if (adjacency::areOpposite(quadOf(run[0]), quadOf(run[1]))) add(run[0], run[1]);
-      return;
-    }
-    std::vector<bool> taken(run.size(), false);
+    taken_.assign(run.size(), false);
     for (std::size_t i = 0; i < run.size(); ++i) {
-      for (std::size_t j = i + 1; j < run.size() && !taken[i]; ++j) {
-        if (taken[j] || !adjacency::areOpposite(quadOf(run[i]), quadOf(run[j]))) continue;
-        taken[i] = taken[j] = true;
+      for (std::size_t j = i + 1; j < run.size() && !taken_[i]; ++j) {
+        if (taken_[j] || !adjacency::areOpposite(quadOf(run[i]), quadOf(run[j]))) continue;
+        taken_[i] = taken_[j] = true;
         add(run[i], run[j]);
       }
     }
@@ -113,6 +107,7 @@ class FacePairs {
   const MeshPart& part_;
   std::span<const BorderCell> around_;
   std::vector<Pairing> pairs_;
+  std::vector<bool> taken_;  ///< of a run
 };
 
 /// Lists the vertices shared with each part.

@@ -139,26 +139,14 @@ class ProvenParts {
 
   [[nodiscard]] PartsInfo info() const { return maker_->info(); }
   /// Makes, proves and delivers all parts.
-  void deliverTo(PartSink& sink, std::size_t tets) {
+  /// @param info  of this
+  void deliverTo(PartSink& sink, const PartsInfo& info) {
     Stage stage(context_, "parts");
-    const std::uint32_t parts = info().parts;
+    stage.setTotal(info.parts);
     const bool inOrder = !sink.takesAnyOrder();
-    const std::uint32_t atOnce = partsAtOnce(info(), tets, inOrder);
-    LoopProgress progress(stage, parts);
-    if (inOrder) return deliverInOrder(sink, atOnce, progress);
-    // So that no more parts than these are in memory, whichever thread works on which.
-    std::atomic<std::uint32_t> next{0};
-    parallelBlocks(nullptr, atOnce, 1, [&](std::size_t, std::size_t, std::size_t) {
-      try {
-        for (std::uint32_t part = next++; part < parts; part = next++) {
-          sink.part(make(part));
-          progress.advance(1);
-        }
-      } catch (...) {
-        next = parts;  // the other threads need not go on
-        throw;
-      }
-    });
+    const std::uint32_t atOnce = partsAtOnce(info, map_.topology.tetCount(), inOrder);
+    inOrder ? deliverInOrder(sink, info.parts, atOnce, stage)
+            : deliverInAnyOrder(sink, info.parts, atOnce, stage);
   }
 
   /// Thread-safe.
@@ -173,14 +161,28 @@ class ProvenParts {
   }
 
  private:
-  void deliverInOrder(PartSink& sink, std::uint32_t atOnce, LoopProgress& progress) {
-    const std::uint32_t parts = info().parts;
+  void deliverInAnyOrder(PartSink& sink, std::uint32_t parts, std::uint32_t atOnce, Stage& stage) {
+    LoopProgress progress(stage, parts);
+    // So that no more parts than these are in memory, whichever thread works on which.
+    std::atomic<std::uint32_t> next{0};
+    parallelBlocks(nullptr, atOnce, 1, [&](std::size_t, std::size_t, std::size_t) {
+      try {
+        for (std::uint32_t part = next++; part < parts; part = next++) {
+          sink.part(make(part));
+          progress.advance(1);
+        }
+      } catch (...) {
+        next = parts;  // the other threads need not go on
+        throw;
+      }
+    });
+  }
+  void deliverInOrder(PartSink& sink, std::uint32_t parts, std::uint32_t atOnce, Stage& stage) {
     std::vector<MeshPart> made(atOnce);
     for (std::uint32_t first = 0; first < parts; first += atOnce) {
       const std::uint32_t count = std::min(atOnce, parts - first);
-      parallelBlocks(&progress, count, 1, [&](std::size_t i, std::size_t, std::size_t) {
-        made[i] = make(first + static_cast<std::uint32_t>(i));
-      });
+      parallelFor(stage, count, 1,
+                  [&](std::size_t i) { made[i] = make(first + static_cast<std::uint32_t>(i)); });
       for (std::uint32_t i = 0; i < count; ++i) {
         MeshPart part = std::exchange(made[i], {});  // freed behind this, whatever the sink does
         sink.part(std::move(part));
@@ -268,7 +270,7 @@ void extractParts(PartSink& sink, const TetMapView& map, const ExtractOptions& o
   parts::runParts(nullptr, sink.neededGhostLayers(), map, options, parts, context, statistics,
                   [&](parts::ProvenParts& maker, const PartsInfo& info) {
                     sink.begin(info);
-                    maker.deliverTo(sink, map.tets.size());
+                    maker.deliverTo(sink, info);
                     sink.end();
                   });
 }

@@ -136,9 +136,9 @@ class AbaqusReader {
   };
   /// Lines that each instance reads, with numbers and names of its own.
   struct Part {
-    const File* file = nullptr;
-    std::size_t begin = 0;
-    std::size_t end = 0;
+    const File* file;
+    std::size_t begin;
+    std::size_t end;
   };
   struct Surface {
     std::string name;
@@ -153,15 +153,15 @@ class AbaqusReader {
 
   const File& add(File&& file) {
     textSize_ += file.text.size();
-    return files_.emplace(keyOf(file.path), std::move(file)).first->second;
+    return files_.emplace(realPath(file.path), std::move(file)).first->second;
   }
-  [[nodiscard]] static std::filesystem::path keyOf(const std::filesystem::path& file) {
+  [[nodiscard]] static std::filesystem::path realPath(const std::filesystem::path& file) {
     std::error_code unknown;
-    std::filesystem::path key = std::filesystem::canonical(file, unknown);
-    return unknown ? file : key;
+    std::filesystem::path path = std::filesystem::canonical(file, unknown);
+    return unknown ? file : path;
   }
 
-  void readLines(Part lines) {
+  void readLines(const Part& lines) {
     constexpr std::uint64_t kMostTimes = 128;
     read_ += lines.end - lines.begin;
     if (read_ > kMostTimes * textSize_) {
@@ -220,15 +220,13 @@ class AbaqusReader {
     std::size_t end = begin;
     for (; nextLine(); end = scanner_->position()) {
       if (!line_.starts_with("*")) continue;
-      std::string keyword = lowerCase(line_.substr(0, line_.find(',')));
-      std::erase_if(keyword, isSpace);
+      const std::string keyword = keywordOf(line_);
       if (keyword == "*endpart") break;
       if (keyword != "*part" && keyword != "*assembly") continue;
       scanner_->moveTo(end);
       break;
     }
-    partNumbers_.emplace(name, parts_.size());
-    parts_.push_back({&file, begin, end});
+    parts_.emplace(name, Part{&file, begin, end});
   }
 
   /// Moves to the next line that is neither blank nor a comment. @return false at the end of the
@@ -248,13 +246,19 @@ class AbaqusReader {
     return false;
   }
 
+  /// The keyword of a line: "* Node" is "*NODE", and "*END INSTANCE" one word.
+  [[nodiscard]] static std::string keywordOf(std::string_view line) {
+    std::string keyword = lowerCase(takeField(line));
+    std::erase_if(keyword, isSpace);
+    return keyword;
+  }
   AbaqusKeyword readKeyword() {
     begun_ = true;
     std::string text(line_);
     while (text.ends_with(',') && nextLine()) text += line_;
     std::string_view rest = text;
-    AbaqusKeyword keyword{lowerCase(takeField(rest)), {}};
-    std::erase_if(keyword.name, isSpace);  // "* Node" is "*NODE", and "*END INSTANCE" one word
+    static_cast<void>(takeField(rest));
+    AbaqusKeyword keyword{keywordOf(text), {}};
     while (!rest.empty()) {
       const std::string_view word = takeField(rest);
       const std::size_t equals = std::min(word.find('='), word.size());
@@ -330,8 +334,8 @@ class AbaqusReader {
       fail("two instances have the name " + quoted(std::string_view(name)));
     }
     longest_ = std::max(longest_, name.size());
-    const auto part = partNumbers_.find(keyword.value("part"));
-    if (part == partNumbers_.end() && keyword.has("part")) {
+    const auto part = parts_.find(keyword.value("part"));
+    if (part == parts_.end() && keyword.has("part")) {
       fail("no part above has the name " + quoted(std::string_view(keyword.value("part"))));
     }
     prefix_ = name + '.';
@@ -344,9 +348,9 @@ class AbaqusReader {
         place_.push_back(word.empty() ? 0 : real(word));
       }
     }
-    if (part == partNumbers_.end()) return;
+    if (part == parts_.end()) return;
     inPart_ = true;
-    readLines(parts_[part->second]);
+    readLines(part->second);
     inPart_ = false;
   }
 
@@ -386,7 +390,7 @@ class AbaqusReader {
     if (name.empty()) fail("*INCLUDE needs the name of a file: INPUT=...");
     if (path.empty()) fail("a text in memory cannot include files", ErrorCode::FileUnsupported);
     const std::filesystem::path file = path.parent_path() / name;
-    const auto known = files_.find(keyOf(file));
+    const auto known = files_.find(realPath(file));
     if (known != files_.end()) return known->second;
     constexpr std::size_t kMost = 1000;
     if (files_.size() > kMost) fail(concat("more than ", kMost, " files are included"));
@@ -798,8 +802,7 @@ class AbaqusReader {
   bool begun_ = false;
   bool isOwn_ = false;  ///< whether this library wrote the file
   int depth_ = 0;       ///< nesting depth of *INCLUDE
-  std::vector<Part> parts_;
-  std::map<std::string, std::size_t> partNumbers_;
+  std::map<std::string, Part> parts_;
   bool inPart_ = false;
   std::map<std::filesystem::path, File> files_;
   const File* main_ = nullptr;

@@ -149,6 +149,9 @@ class CgnsReader {
   [[nodiscard]] static std::string nameOf(const std::string& path) {
     return path.substr(path.rfind('/') + 1);
   }
+  [[nodiscard]] static std::string parentOf(const std::string& path) {
+    return path.substr(0, path.rfind('/'));
+  }
   [[nodiscard]] std::string textOf(const std::string& path) const {
     std::string text = file_->text(path + "/ data");
     text.resize(std::min(text.find('\0'), text.size()));
@@ -330,7 +333,7 @@ class CgnsReader {
           readStructured(zone, condition, location, std::move(group));
           continue;
         }
-        const bool ofVertices = location.empty() || location == "Vertex";
+        const bool ofVertices = isOfVertices(location);
         readRanges(condition, "Point", ofVertices ? zone.points : zone.last, group);
         if (ofVertices && !group.ranges.empty()) {
           addNodes(zone, group);
@@ -348,11 +351,16 @@ class CgnsReader {
     }
   }
 
+  /// Where conditions and connections are, if they do not say so.
+  [[nodiscard]] static bool isOfVertices(const std::string& location) {
+    return location.empty() || location == "Vertex";
+  }
+
   /// Conditions of structured zones name faces, by the vertices of a plane or by their lowest
   /// corners; or other vertices; or cells.
   void readStructured(const Zone& zone, const std::string& condition, const std::string& location,
                       Group group) {
-    const bool ofVertices = location.empty() || location == "Vertex";
+    const bool ofVertices = isOfVertices(location);
     const bool ofCells = location == "CellCenter";
     if (!ofVertices && !ofCells && !location.ends_with("FaceCenter")) return;
     Group faces{group.name, {}};
@@ -401,8 +409,7 @@ class CgnsReader {
   [[nodiscard]] std::string nameByFamily(const Zone& zone, const std::string& condition) const {
     const std::string family = textIn(condition, "FamilyName_t");
     if (family.empty()) return nameOf(condition);
-    const std::string base = zone.path.substr(0, zone.path.rfind('/'));
-    const std::vector<std::string> found = nodes(base, "Family_t", family);
+    const std::vector<std::string> found = nodes(parentOf(zone.path), "Family_t", family);
     const std::string above = found.empty() ? std::string() : textIn(found[0], "FamilyName_t");
     return above.empty() ? family : above;
   }
@@ -511,10 +518,8 @@ class CgnsReader {
   /// @param byRange  between ranges of two structured zones
   [[nodiscard]] std::vector<std::pair<Index, Index>> sharedBy(Zone& zone, const std::string& path,
                                                               bool byRange) {
-    const std::string location = textIn(path, "GridLocation_t");
-    const bool ofVertices = location.empty() || location == "Vertex";
     const bool abuts = byRange || textIn(path, "GridConnectivityType_t") == "Abutting1to1";
-    if (!ofVertices || !abuts) return {};
+    if (!abuts || !isOfVertices(textIn(path, "GridLocation_t"))) return {};
     for (const std::string& property : nodes(path, "GridConnectivityProperty_t")) {
       if (!nodes(property, "Periodic_t").empty()) return {};
     }
@@ -574,7 +579,7 @@ class CgnsReader {
   }
   /// The zone that a connection names, perhaps with the base in front; null if there is none.
   [[nodiscard]] Zone* zoneNamed(const std::string& donor, const Zone& from) {
-    const std::string base = from.path.substr(0, from.path.rfind('/') + 1);
+    const std::string base = parentOf(from.path) + '/';
     const auto find = [this](const auto& fits) {
       const auto found = std::find_if(zones_.begin(), zones_.end(), fits);
       return found == zones_.end() ? nullptr : &*found;

@@ -68,14 +68,12 @@ void appendNodes(const LagrangeMesh& mesh, std::uint64_t cell,
                  const std::array<std::size_t, 3>& corners, const std::vector<Node>& list,
                  Array<Index>& nodes) {
   const Index* const ofCell = mesh.nodes.data() + cell * mesh.nodesPerCell();
-  const std::ptrdiff_t row = mesh.order + 1;
-  const auto placeOf = [row](const Node& n) { return n[0] + row * (n[1] + row * n[2]); };
-  const std::ptrdiff_t from = placeOf(corner(corners[0], 0, mesh.order));
+  const int from = nodePlace(corner(corners[0], 0, mesh.order), mesh.order);
   const auto stepTo = [&](std::size_t other) {
-    return (placeOf(corner(other, 0, mesh.order)) - from) / mesh.order;
+    return (nodePlace(corner(other, 0, mesh.order), mesh.order) - from) / mesh.order;
   };
-  const std::ptrdiff_t stepI = stepTo(corners[1]);
-  const std::ptrdiff_t stepJ = stepTo(corners[2]);
+  const int stepI = stepTo(corners[1]);
+  const int stepJ = stepTo(corners[2]);
   for (const Node& n : list) nodes.push_back(ofCell[from + n[0] * stepI + n[1] * stepJ]);
 }
 

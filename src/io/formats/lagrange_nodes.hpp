@@ -34,22 +34,27 @@ using Node = std::array<int, 3>;
   return nodes;
 }
 
-/// Indices in the order of LagrangeMesh, i + (p + 1) (j + (p + 1) k).
+/// The index of a node in the order of LagrangeMesh, i + (p + 1) (j + (p + 1) k).
+[[nodiscard]] constexpr int nodePlace(const Node& n, int order) {
+  return n[0] + (order + 1) * (n[1] + (order + 1) * n[2]);
+}
 [[nodiscard]] inline std::vector<std::uint32_t> placesOf(const std::vector<Node>& nodes,
                                                          int order) {
   std::vector<std::uint32_t> places;
   places.reserve(nodes.size());
-  for (const Node& n : nodes) {
-    places.push_back(static_cast<std::uint32_t>(n[0] + (order + 1) * (n[1] + (order + 1) * n[2])));
-  }
+  for (const Node& n : nodes) places.push_back(static_cast<std::uint32_t>(nodePlace(n, order)));
   return places;
 }
 
-/// The order of cells with (p + 1)^3 nodes; 0 if there is no such p from 1 to 9.
+/// The number of nodes of a cell, (p + 1)^3.
+[[nodiscard]] constexpr std::size_t nodesOfOrder(int order) {
+  const auto n = static_cast<std::size_t>(order) + 1;
+  return n * n * n;
+}
+/// The order of cells with so many nodes; 0 if there is none from 1 to 9.
 [[nodiscard]] constexpr int orderOfNodes(std::uint64_t nodes) {
   for (int order = 1; order <= kMaxOrder; ++order) {
-    const auto n = static_cast<std::uint64_t>(order) + 1;
-    if (n * n * n == nodes) return order;
+    if (nodesOfOrder(order) == nodes) return order;
   }
   return 0;
 }

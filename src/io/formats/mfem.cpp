@@ -71,11 +71,6 @@ std::optional<MfemSpace> mfemSpace(std::string_view name) {
   return std::nullopt;
 }
 
-std::size_t mfemNodes(int order) {
-  const auto n = static_cast<std::size_t>(order) + 1;
-  return n * n * n;
-}
-
 /// Row i: the polynomials that are 1 at one of the points of Gauss and Lobatto in [0, 1] and 0 at
 /// the others, at i / order.
 std::vector<double> valuesFromLobatto(int order) {
@@ -123,7 +118,7 @@ class FirstMet {
 /// smaller vertex of an edge, and as the first cell of a face lists its vertices.
 class NodeNumbers {
  public:
-  explicit NodeNumbers(int order) : order_(order), slots_(mfemNodes(order)) {
+  explicit NodeNumbers(int order) : order_(order), slots_(nodesOfOrder(order)) {
     const std::vector<std::uint32_t> places = vtkNodeOrder(order);
     for (std::size_t k = 0; k < places.size(); ++k) slots_[places[k]] = k;
   }
@@ -174,11 +169,8 @@ class NodeNumbers {
       }
     }
   }
-  /// With x fastest, of a cell of one step.
-  [[nodiscard]] int placeOf(std::size_t k) const {
-    const Node node = corner(k, 0, 1);
-    return node[0] + (order_ + 1) * (node[1] + (order_ + 1) * node[2]);
-  }
+  /// Of a corner of a cell of one step.
+  [[nodiscard]] int placeOf(std::size_t k) const { return nodePlace(corner(k, 0, 1), order_); }
 
   int order_;
   std::vector<std::size_t> slots_;  ///< in VTK's order, of nodes with x fastest
@@ -232,7 +224,7 @@ class MfemReader {
     if (at < text.size()) scanner_.moveTo(at + kMfemCollection.size());
     std::optional<MfemSpace> space;
     if (at < text.size()) space = mfemSpace(scanner_.readToken());
-    const std::size_t nodesEach = mfemNodes(space ? space->order : 1);
+    const std::size_t nodesEach = nodesOfOrder(space ? space->order : 1);
     const std::size_t block = lists_.blockOf(volumeCells("hexahedra", nodesEach), nodesEach);
     lists_.blocks[block].numbers = {0};
     return std::move(lists_);
@@ -347,7 +339,7 @@ class MfemReader {
 
   /// Reads the nodes, and makes the cells list them.
   void placeNodes(const MfemSpace& space, bool byNode) {
-    const std::size_t each = mfemNodes(space.order);
+    const std::size_t each = nodesOfOrder(space.order);
     if (space.order > 1 || space.perCell) requireHexahedraOnly();
     ElementBlock none;
     ElementBlock& cells = lists_.blocks.empty() ? none : lists_.blocks[0];
@@ -392,13 +384,11 @@ class MfemReader {
   }
 
   void requireFinite(const std::vector<Vec3>& nodes, std::size_t cell) const {
-    for (const Vec3& node : nodes) {
-      for (const double x : node) {
-        if (std::isfinite(x)) continue;
-        scanner_.fail(ErrorCode::NotFinite, Place{PlaceKind::Cell, cell}, "a node of cell ", cell,
-                      " is not finite between the places that the file gives.");
-      }
+    if (std::all_of(nodes.begin(), nodes.end(), [](const Vec3& node) { return isFinite(node); })) {
+      return;
     }
+    scanner_.fail(ErrorCode::NotFinite, Place{PlaceKind::Cell, cell}, "a node of cell ", cell,
+                  " is not finite between the places that the file gives.");
   }
 
   void requireHexahedraOnly() const {
@@ -422,7 +412,7 @@ class MfemReader {
 
   /// Adds nodes of edges, faces and cells, in this order.
   void addNodes(ElementBlock& cells, int order) {
-    const std::size_t each = mfemNodes(order);
+    const std::size_t each = nodesOfOrder(order);
     const auto inner = static_cast<std::size_t>(order) - 1;  // nodes of an edge
     const Array<Index> corners = std::exchange(cells.nodes, {});
     const std::size_t count = cells.count();
